@@ -349,19 +349,33 @@ bool Boundary::holds(int axis, int side) const {
   return !gates_->outflow_at(axis, side, middle);
 }
 
+// Ways across thin bodies count, and solids have no such bound. Wedges reach farther than a gap.
+bool Boundary::has_no_quick_bound() const {
+  return solids_ != nullptr || gates_ != nullptr || (bodies_ != nullptr && bodies_->thin() != nullptr);
+}
+
+bool Boundary::clear_of_bodies(const Vec3& place) const {
+  return bodies_ == nullptr || bodies_->surely_farther(place, narrowest_wedge * spacing_);
+}
+
 bool Boundary::clear_of_sides(const Vec3& place) const {
-  if (has_obstacles() || gates_ != nullptr) return false;
+  if (has_no_quick_bound()) return false;
   for (int axis = 0; axis < domain_.dimensions; ++axis)
     if (!(place[axis] > walls[axis][0] + gap() && place[axis] < walls[axis][1] - gap())) return false;
-  return true;
+  return clear_of_bodies(place);
 }
 
 bool Boundary::clear_of_sides(const WallPositions& at, const std::array<const double*, 3>& places, std::size_t first,
                               std::size_t last) const {
-  if (has_obstacles() || gates_ != nullptr) return false;
+  if (has_no_quick_bound()) return false;
   for (int axis = 0; axis < domain_.dimensions; ++axis)
     if (!domain_.periodic(axis) && any_outside(places[axis], first, last, at[axis][0] + gap(), at[axis][1] - gap()))
       return false;
+  for (std::size_t i = first; i < last && bodies_ != nullptr; ++i) {
+    Vec3 place{};
+    for (int axis = 0; axis < domain_.dimensions; ++axis) place[axis] = places[axis][i];
+    if (!clear_of_bodies(place)) return false;
+  }
   return true;
 }
 

@@ -171,8 +171,8 @@ class Boundary {
 
   // How near to a wall points may come.
   double gap() const;
-  // Whether apply_walls() and hold_liquid() would leave a place as it is: before all sides, in scenes without bodies
-  // and openings; false where that is not seen at once.
+  // Whether apply_walls() and hold_liquid() would leave a place as it is: before all sides and far from bodies, in
+  // scenes without thin bodies, solids and openings; false where that is not seen at once.
   bool clear_of_sides(const Vec3& place) const;
   // Of places first .. last - 1, which may be beyond periodic sides, for walls at `at`.
   bool clear_of_sides(const WallPositions& at, const std::array<const double*, 3>& places, std::size_t first,
@@ -184,6 +184,8 @@ class Boundary {
   double bytes() const;
 
  private:
+  bool has_no_quick_bound() const;
+  bool clear_of_bodies(const Vec3& place) const;
   void keep_before_sides(const WallPositions& at, int axis, Vec3& position, Vec3* velocity) const;
   void unite_solids(const WallPositions& at);
   // Boxes and wall points of bodies as they are behind sides that are there.
