@@ -357,14 +357,12 @@ void continuity_sweep(const SweepContext& context, PackedNeighbours& packed, con
       if (fields.viscosity == nullptr && fields.common_viscosity == 0)
         return with.template operator()<Drag::none, false>();
       if constexpr (phases != Phases::one)
-        if (fields.viscosity != nullptr)
+        if (phases == Phases::several || fields.viscosity != nullptr)
           return fields.friction == nullptr ? with.template operator()<Drag::of_viscosities, false>()
                                             : with.template operator()<Drag::of_viscosities, true>();
       if constexpr (phases != Phases::several)
         return fields.friction == nullptr ? with.template operator()<Drag::of_one_viscosity, false>()
                                           : with.template operator()<Drag::of_one_viscosity, true>();
-      else
-        throw std::logic_error("several phases need the viscosity of each particle");
     };
     const auto of = [&]<Phases phases>() {
       if (fields.shift[0] != nullptr)
@@ -374,7 +372,9 @@ void continuity_sweep(const SweepContext& context, PackedNeighbours& packed, con
       else
         run.template operator()<phases, false, false>();
     };
-    if (fields.phase == nullptr)
+    // A viscosity of all is that of one phase, in which without walls nothing differs.
+    const bool of_one_phase = fields.viscosity == nullptr && fields.common_viscosity > 0;
+    if (fields.phase == nullptr || (of_one_phase && context.walls == nullptr))
       of.template operator()<Phases::one>();
     else if (context.walls != nullptr)
       of.template operator()<Phases::beside_walls>();

@@ -45,6 +45,8 @@ class BodyForces {
     const float* viscosity = nullptr;                      // of each particle; null: dynamic_viscosity of all
     std::function<double(std::size_t)> density, pressure;  // of a particle
   };
+  // Of a particle: place, velocity, pressure and density.
+  static constexpr double bytes_read(int dimensions) { return (2 * dimensions + 1) * sizeof(double) + sizeof(float); }
   // Per [[body]] entry; zero for those that are no walls.
   std::vector<SurfaceForce> measure(const Fields& fields, double t) const;
   // For methods that add up what each particle exerts on walls: of bodies with gaps the pressure, which is missing

@@ -88,7 +88,8 @@ void Gfd::step(double dt, Ledger& ledger) {
     throw;
   }
   if (work_of_bodies_ && WorkOfBodies::due(flow_.steps)) {
-    const Ledger::Scope timed = ledger.time("work of bodies");
+    const double n = static_cast<double>(flow_.size());
+    const Ledger::Scope timed = ledger.time("work of bodies", n, 0, n * BodyForces::bytes_read(flow_.dimensions));
     forces_on_bodies();
   }
 }

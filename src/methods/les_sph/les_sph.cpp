@@ -96,7 +96,8 @@ void LesSph::step(double dt, Ledger& ledger) {
   sampled_step_ = -1;  // sorting changes what the bins of the sampler refer to, also when the step is refused
   plan_.run_step(dt, static_cast<double>(flow_.size()), ledger);
   if (work_of_bodies_ && WorkOfBodies::due(flow_.steps)) {
-    const Ledger::Scope timed = ledger.time("work of bodies");
+    const double n = static_cast<double>(flow_.size());
+    const Ledger::Scope timed = ledger.time("work of bodies", n, 0, n * BodyForces::bytes_read(flow_.dimensions));
     forces_on_bodies();
   }
   remark_bodies_that_collide();
