@@ -12,7 +12,7 @@ from unittest import mock
 
 import paths
 import numpy as np
-from spume_tools.plots import probes
+from spume_tools.plots import probes, series
 from spume_tools.results import Results
 from synthetic import lattice, new_folder, series_of, write_case, write_snapshots, write_table
 
@@ -59,6 +59,19 @@ class Plotting(Scratch):
         self.assertEqual(names, {"energy.png", "numerics.png", "speed.png", "pressure.png", "spectrum.png", "probes.png",
                                  "line_centre.png", "kinetic_energy_exact.png"})
         self.assertEqual(complaints, "")
+
+    def test_the_power_of_ten_of_an_energy_is_beside_the_names_of_its_curves(self):
+        folder = new_folder(self.path, "run")
+        write_case(folder, "Much energy", [0, 0], [1, 1], 0.1)
+        write_table(folder / "series.csv", series_of([0, 1.0], kinetic_energy=[0, 2e6], potential_energy=[1e6, -2e6]))
+        with mock.patch.object(series, "finish", side_effect=lambda figure, *_: figure):
+            figure, = series.plot_energy(Results(folder), folder)
+        figure.tight_layout()
+        figure.canvas.draw()
+        left = figure.axes[0]
+        power = left.yaxis.get_offset_text()
+        self.assertEqual(power.get_text(), "1e6")
+        self.assertFalse(left.get_legend().get_window_extent().overlaps(power.get_window_extent()))
 
     def test_areas_of_planes_are_no_elevations(self):
         folder = new_folder(self.path, "run")

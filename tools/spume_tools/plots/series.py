@@ -20,7 +20,8 @@ def plot_energy(run, out):
         left.plot(t, series["potential_energy"] - rest, label="potential, change from the start")
         left.plot(t, series["kinetic_energy"] + series["potential_energy"] - rest, "k", label="sum")
     left.set(xlabel=series.label("t"), ylabel=series.label("kinetic_energy") if not has_potential else series.label("kinetic_energy").replace("kinetic ", ""))
-    left.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3, columnspacing=1, handlelength=1.4)  # above: curves fill the frame
+    # Above, as curves fill the frame, and above the power of ten that the axis has there.
+    left.legend(loc="lower left", bbox_to_anchor=(0, 1.05), ncols=3, columnspacing=1, handlelength=1.4)
     if dissipates:
         axes[0, 1].plot(t, series["dissipation"], color="C3")
         axes[0, 1].set(xlabel=series.label("t"), ylabel=series.label("dissipation"))
